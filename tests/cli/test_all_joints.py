@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Several joints of a log: which are meant by --joint, and that each gives what it gives alone."""
+"""Several joints of a log: each gives what it gives alone."""
 
 import csv
 import io
 import json
-import math
 
-from commands import GEAR, OF_A_LOG, Case, SharedCase, asked, ended
+from commands import OF_A_LOG, Case, SharedCase, asked
+from logs import wide
 
 # Those that take several joints, with what each gives: a document with `joints`, or CSV with a column `joint`.
 LISTS = {
@@ -16,27 +16,6 @@ LISTS = {
 }
 CSV = {"spectrum": ["--bins"], "spectrum --segment": ["--bins"], "spectrum --domain order": ["--bins"], "spectrum --map campbell": [], "spectrum --track": []}
 HEAD = ("schema", "tool", "version", "command", "inputs", "recording", "recordings")
-
-
-def wide_log(joints=("j1", "j2", "j3"), rows=4000, without=()):
-    """Joints that move through all speeds, each with ripple of its own. `without`: columns that are not there."""
-    lines = ["time_s," + ",".join(name for joint in joints for name in columns_of(joint) if name not in without)]
-    position = [0.0] * len(joints)
-    for k in range(rows):
-        cells = [f"{k / 1000:.3f}"]
-        for j, joint in enumerate(joints):
-            speed = 90 + 60 * math.sin(k / 500 + j)
-            ripple = 0.5 / (j + 1) * math.cos(math.radians(100 * position[j])) + 0.2 * math.cos(math.radians(200 * position[j]))
-            noise = 0.02 * math.sin(7.3 * k * k + j)
-            values = (speed, 3 * math.sin(k / 900) + ripple + noise, position[j])
-            cells += [f"{value:.5f}" for name, value in zip(columns_of(joint), values) if name not in without]
-            position[j] += speed / 1000
-        lines.append(",".join(cells))
-    return "\n".join(lines) + "\n"
-
-
-def columns_of(joint):
-    return f"{joint}_velocity_deg_s", f"{joint}_torque_nm", f"{joint}_position_deg"
 
 
 def without_head(document):
@@ -53,7 +32,7 @@ class EachAsAlone(SharedCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        (cls.folder / "wide.csv").write_text(wide_log())
+        (cls.folder / "wide.csv").write_text(wide(["j1", "j2", "j3"]))
 
     def alone(self, name, joint, *more):
         return self.good(*asked(name, "wide.csv"), "--joint", joint, *more).stdout
@@ -127,112 +106,12 @@ class EachAsAlone(SharedCase):
             self.assertEqual({n: v for n, v in without_head(one).items() if n != "joint"}, {n: v for n, v in alone.items() if n != "joint"})
 
 
-class Selection(Case):
-    """--joint: names, numbers, lists and ranges."""
-
-    def taken(self, *words, log="wide.csv"):
-        return [line.split(":")[0] for line in self.good("spectrum", log, "-q", *words).stdout.splitlines() if ": " in line[:20]]
-
-    def write(self, name, text):
-        (self.folder / name).write_text(text)
-
-    def test_lists_ranges_and_repeats(self):
-        self.write("wide.csv", wide_log(("j1", "j2", "j3", "j4"), 600))
-        for words, joints in ((["--joint", "j1,j3"], "j1 j3"), (["--joint", "j2-j4"], "j2 j3 j4"), (["--joint", "2-3,j1"], "j1 j2 j3"),
-                              (["--joint", "j4", "--joint", "1"], "j1 j4"), (["--joint", "joint2,3"], "j2 j3"),
-                              (["--joint", "all"], "j1 j2 j3 j4"), ([], "j1 j2 j3 j4"), (["--joint", "3,3,j1"], "j1 j3")):
-            with self.subTest(words):
-                self.assertEqual(self.taken(*words), joints.split())
-
-    def test_a_number_is_that_of_the_log(self):
-        self.write("zero.csv", wide_log(("arm_joint0", "arm_joint1", "arm_joint2"), 600))
-        self.assertEqual(self.taken("--joint", "0,arm_joint2", log="zero.csv"), ["arm_joint0", "arm_joint2"])
-        self.assertEqual(self.taken("--joint", "1-2", log="zero.csv"), ["arm_joint1", "arm_joint2"])
-
-    def test_what_is_wrong_names_the_joints_that_there_are(self):
-        self.write("wide.csv", wide_log(rows=300))
-        for words, said in ((["j1,j7"], "no joint 'j7'"), (["j7"], "no joint 'j7'"), (["j1-j7"], "no joint 'j1-j7'"), (["j1,,j2"], "no joint ''"),
-                            (["j3-j1"], "runs backwards"), (["j1", "--joint", "elbow"], "no joint 'elbow'")):
-            for command in ("info", "spectrum", "identify", "filter", "map", "diagnose", "compare", "spectrum --track", "recommend"):
-                with self.subTest(words=words, command=command):
-                    ended(2, self.run_tool(*asked(command, "wide.csv"), "--joint", *words), said, "j1, j2, j3")
-
-    def test_what_is_of_one_joint_says_so(self):
-        self.write("wide.csv", wide_log(rows=1500))
-        for command in ("spectrum", "spectrum --track", "compare", "identify"):
-            with self.subTest(command):
-                if command == "identify":  # draws which motor is in which torque
-                    self.good(*asked(command, "wide.csv"), "--plot", "a.json")
-                    self.assertEqual(json.loads((self.folder / "a.json").read_text())["name"], "motor-matrix")
-                else:
-                    ended(2, self.run_tool(*asked(command, "wide.csv"), "--plot", "a.json"), "a picture shows one joint")
-                self.good(*asked(command, "wide.csv"), "--plot", f"{command}_{{joint}}.json")
-                self.assertTrue((self.folder / f"{command}_j2.json").exists())
-        ended(2, self.run_tool(*asked("spectrum --track", "wide.csv"), "-o", "a.npy"), "put {joint} into the name")
-        self.good(*asked("spectrum --track", "wide.csv"), "-o", "a_{joint}.npy")
-        self.assertTrue((self.folder / "a_j3.npy").exists())
-
-
-class LeftOut(Case):
-    """A joint without what a command needs is left out with a warning; where none is left, it is an error."""
-
-    def setUp(self):
-        super().setUp()
-        (self.folder / "wide.csv").write_text(wide_log(without=("j2_torque_nm",)))
-
-    def test_no_torque(self):
-        for command in ("spectrum", "spectrum --track", "compare", "identify", "recommend", "filter"):
-            for words in (["--joint", "all"], ["--joint", "j1-j3"]):
-                with self.subTest(command=command, words=words):
-                    done = self.good(*asked(command, "wide.csv"), *words)
-                    self.assertIn("warning: joint j2 is left out: it has no torque", done.stderr)
-                    self.assertEqual(done.stderr.count("left out: it has no torque"), 1)
-            ended(2, self.run_tool(*asked(command, "wide.csv"), "--joint", "j2"), "it has no torque")
-
-    def test_no_table_or_joint_file(self):
-        self.good("design", *GEAR, "--sample-rate", "1kHz", "--speed", "20:180:20", "--q", "1", "-o", "table_j1.json", "--json")
-        words = ("filter", "wide.csv", "--joint", "all", "--method", "switching,table=table_{joint}.json")
-        done = self.good(*words, "-o", "all.csv")
-        self.assertIn("joint j3 is left out: table_j3.json", done.stderr)
-        self.good("filter", "wide.csv", "--joint", "j1", "--method", "switching,table=table_j1.json", "-o", "one.csv")
-        self.assertEqual((self.folder / "all.csv").read_bytes(), (self.folder / "one.csv").read_bytes())
-        (self.folder / "table_j1.json").unlink()
-        self.assertEqual(self.run_tool(*words, "-o", "none.csv").returncode, 4)
-        self.assertFalse((self.folder / "none.csv").exists())
-        self.good("identify", "wide.csv", "--joint", "j1", "-o", "found_j1.json")
-        done = self.good("spectrum", "wide.csv", "--track", "--joint-file", "found_{joint}.json", "-o", "track.csv")
-        self.assertIn("joint j3 is left out: found_j3.json", done.stderr)
-        self.assertEqual({row[0] for row in rows_of((self.folder / "track.csv").read_text())}, {"joint", "j1"})
-
-    def test_nothing_is_left(self):
-        done = ended(4, self.run_tool("spectrum", "wide.csv", "--track", "--joint-file", "found_{joint}.json"))
-        self.assertEqual(done.stdout, "")
-
-
-class SaidOnce(Case):
-    """What is said of several joints in the same words is said once."""
-
-    def test_the_same_warning(self):
-        text = wide_log(rows=1500).split("\n")
-        (self.folder / "wide.csv").write_text("\n".join(text))
-        done = self.good("compare", "wide.csv", "--method", "lowpass,cutoff=5Hz,order=1")
-        self.assertEqual(done.stderr.count("no line is known"), 1, done.stderr)
-        self.assertNotIn("joint j", done.stderr)
-
-    def test_of_some_joints_with_their_names(self):
-        (self.folder / "wide.csv").write_text(wide_log(rows=1500, without=("j1_position_deg", "j3_position_deg")))
-        done = self.good("spectrum", "wide.csv", "--track", *GEAR, "-o", "track.csv")
-        self.assertEqual([line for line in done.stderr.splitlines() if "no usable position" in line],
-                         ["ripplenotch: warning: joints j1, j3: no usable position: the angle is integrated velocity, and phases "
-                          "count from the first sample"])
-
-
 class Currents(Case):
     """A motor current without --kt: everything is in A, and says so."""
 
     def setUp(self):
         super().setUp()
-        (self.folder / "amps.csv").write_text(wide_log(("j1", "j2")).replace("_torque_nm", "_current_A"))
+        (self.folder / "amps.csv").write_text(wide(["j1", "j2"]).replace("_torque_nm", "_current_A"))
 
     def test_reports_and_documents(self):
         for name in ("compare", "recommend", "spectrum", "identify", "map", "info"):

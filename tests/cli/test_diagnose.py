@@ -48,21 +48,3 @@ class Diagnose(Case):
         self.assertAlmostEqual(summary["along_log"]["residual_rms_nm"], gap["validation_after_nm"], delta=1e-6)
         self.assertEqual(json.loads((self.folder / "improved.json").read_text())["effects"],
                          found["model"]["effects"])
-
-    def test_the_old_spelling_of_improved_model_is_taken_with_a_warning_and_stands_in_no_help(self):
-        self.log("log.csv", move(0, 120))
-        words = ("diagnose", "log.csv", "--model", "model.json")
-        expected = self.run_tool(*words, "--improved-model", "improved.json")
-        self.assertEqual((expected.returncode, expected.stderr), (0, ""))
-        warning = ("ripplenotch: warning: --output of diagnose will mean the result; write --improved-model FILE\n")
-        for spelling, said in ((("-o", "old.json"), warning), (("-oold.json",), warning), (("--output", "old.json"), warning),
-                               (("--output=old.json",), warning), (("-qo", "old.json"), "")):
-            with self.subTest(spelling):
-                done = self.run_tool(*words, *spelling, "--force")
-                self.assertEqual((done.returncode, done.stdout, done.stderr), (0, expected.stdout, said))
-                self.assertEqual((self.folder / "old.json").read_bytes(), (self.folder / "improved.json").read_bytes())
-        ended(2, self.run_tool(*words, "-o", "a.json", "--improved-model", "b.json"), "--improved-model is given more than once")
-        told = self.run_tool(*words, "--improved-model", "-")
-        self.assertEqual((told.returncode, told.stdout), (2, ""))
-        self.assertIn("--improved-model -: the result goes to standard output; give a file", told.stderr)
-        self.assertNotRegex(self.run_tool("diagnose", "--help-all").stdout, r"-o\b|--output\b")

@@ -214,20 +214,6 @@ class Simulated(Case):
             self.assertEqual(short.returncode, 0, short.stderr)
             self.assertEqual(json.loads(short.stdout)["gap"], json.loads(long.stdout)["gap"])
 
-    def test_refusals_say_what_is_wrong(self):
-        ratio = ["--gear-ratio", "100"]
-        for words, code, part in (
-                (["--simulated", "column,name=tau", *ratio], 2, "no column 'tau'"),
-                (["--simulated", "column,name=torque_nm", *ratio], 3, "is the measured torque"),
-                (["--simulated", "column,name=tau_model_nm"], 2, "--gear-ratio is missing"),
-                (["--simulated", "tau", *ratio], 2, "no column 'tau'"),
-                (["--simulated", "log.csv", *ratio], 2, "--simulated log,file=log.csv,column=NAME"),
-                (["--simulated", "tau_model_nm,delay=fit", *ratio], 2, "delay=fit is not needed"),
-                (["--simulated", "tau_model_nm,friction=fit", *ratio], 2, "no key 'friction'"),
-                (["--simulated", "colum,name=tau_model_nm", *ratio], 2, "neither column,name=NAME nor log"),
-                (ratio, 2, "--model is missing")):
-            ended(code, self.run_tool("diagnose", "log.csv", *words), part)
-
 
 RIPPLE = ("--ripple", "1:0.6Nm:30deg", "--ripple", "2:0.9Nm:-40deg")
 FRICTION = ("--effect", "coulomb-friction,torque_nm=1.5,width_deg_s=1", "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.03")

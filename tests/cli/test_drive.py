@@ -88,20 +88,6 @@ class Drive(Case):
         self.assertAlmostEqual(json.loads(again.stdout)["along_log"]["measured_rms_nm"], told["rms_nm"], delta=1e-4)
         self.assertAlmostEqual(told["rms_nm"], float(words.split()[1]), delta=0.01)
 
-    def test_what_cannot_be_is_refused_with_the_remedy(self):
-        write_log(self.folder / "log.csv", 0.0, seconds=2.0)
-        for law, message in (("pid,kp=1", "no control law"), ("pd,kp=1", "needs command=...: column of the position"),
-                             ("pd,command=target_rad", "needs kp=...: Nm/rad"), ("pd,kp=0,command=target_rad", "kp: 0 is not above 0"),
-                             ("pd,kp=1,command=aim", "--drive pd, command: log.csv has no column 'aim'"),
-                             ("pd,kp=1,command=position_rad", "'position_rad' is the position of the log"),
-                             (LAW + ",velocity-command=aim", "--drive pd, velocity-command: log.csv has no column"),
-                             (LAW + ",delay=soon", "delay: cannot read 'soon'"), (LAW + ",delay=4", "delay: 4 is not from 0 to 1 s"),
-                             (LAW + ",limit=-1Nm", "limit: -1Nm is not above 0 Nm")):
-            with self.subTest(law=law):
-                done = ended(2, self.run_tool("diagnose", "log.csv", "--model", "m.json", "--drive", law, "-q"), message)
-                self.assertEqual(done.stderr.count("\n"), 1)
-        ended(2, self.run_tool("simulate", "--gear-ratio", "100", "--motion", "rest,duration=1s", "--sample-rate", "1kHz", "--drive", LAW), "needs a LOG")
-
     @unittest.skipUnless(BAM.is_dir(), "the logs of published models are not here")
     def test_a_published_model_is_found_behind_its_control_law(self):
         # BAM's M1 of eRob80:100 at its first gain; truth: 5.611 Nm, 8.392 Nm s/rad, 40.21 Nm.

@@ -29,9 +29,6 @@ class InFolder(Case):
     def hash_of(self, name):
         return hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
 
-    def entries(self):
-        return {path.name: path.read_bytes() for path in self.folder.iterdir() if path.is_file()}
-
 
 class Hashes(InFolder):
     def test_a_result_that_tells_a_hash_has_it_whichever_way_it_is_asked_for(self):
@@ -148,38 +145,6 @@ class LogsThatChangeBetweenPasses(InFolder):
 
     def test_one_that_ends_early_is_refused(self):
         self.refuse(lambda path: os.truncate(path, self.size // 2))
-
-
-class Collisions(InFolder):
-    """Refused with exit code 2 before anything is done, --force or not."""
-
-    def refuse(self, *words):
-        for force in ((), ("--force",)):
-            before = self.entries()
-            done = self.run_tool(*words, *force)
-            self.assertEqual(done.returncode, 2, f"{words}: {done.stderr}")
-            self.assertEqual(self.entries(), before, words)
-            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-
-    def setUp(self):
-        super().setUp()
-        ended(0, self.run_tool("design", *GEAR, "--sample-rate", "1kHz", "--speed", "18:180:18", "--json", "-o", "table.json"))
-        os.symlink("table.json", self.folder / "link.json")
-        os.link(self.folder / "log.csv", self.folder / "same.csv")
-
-    def test_an_output_that_is_an_input(self):
-        for words in (("filter", "log.csv", "--method", "switching,table=table.json", "-o", "table.json"),
-                      ("filter", "log.csv", "--method", "switching,table=table.json", "-o", "link.json"),
-                      ("filter", "log.csv", "--method", "switching,table=table.json", "-o", "out.csv", "--metrics", "table.json"),
-                      ("filter", "log.csv", *LOWPASS, "-o", "log.csv"),
-                      ("filter", "log.csv", *LOWPASS, "-o", "same.csv"),
-                      ("filter", "log.csv", *LOWPASS, "-o", "out.csv", "--metrics", "log.csv"),
-                      ("spectrum", "log.csv", "-o", "log.csv"),
-                      ("spectrum", "log.csv", "--track", *GEAR, "-o", "log.csv"),
-                      ("export", "table.json", "--to", "scipy", "-o", "table.json"),
-                      ("compare", "log.csv", *GEAR, "--json", "-o", "table.json", "--method", "switching,table=table.json"),
-                      ("report", "table.json", "-o", "table.json")):
-            self.refuse(*words)
 
 
 class Places(InFolder):

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""ripplenotch filter as its users meet it: bytes that pass, gaps, rates, metrics, errors that leave nothing behind."""
+"""ripplenotch filter as its users meet it: bytes that pass, decimals, threads."""
 
-import json
 import math
 import re
 
 import commands
 from commands import DATA, ended
-from logs import sine
 
 LOWPASS = "lowpass,cutoff=13rad/s"
 
@@ -15,26 +13,10 @@ LOWPASS = "lowpass,cutoff=13rad/s"
 class Case(commands.Case):
     bytes_out = True
 
-    def refused(self, code, *words, stdin=None):
-        done = self.run_tool(*words, stdin=stdin)
-        message = done.stderr.decode()
-        self.assertEqual(done.returncode, code, message)
-        self.assertEqual(len(message.splitlines()), 1, message)
-        return message
-
     def write(self, name, text):
         path = self.folder / name
         path.write_bytes(text.encode() if isinstance(text, str) else text)
         return path
-
-    def table(self, *words):
-        words = words or ("--sample-rate", "1kHz", "--speed", "18:180:18")
-        self.good("design", "--gear-ratio", 100, "--orders", "1,2", *words, "-o", "table.json", "--force")
-        return self.folder / "table.json"
-
-    def metrics(self, log, *words):
-        self.good("filter", log, *words, "-o", "out.csv", "--metrics", "metrics.json", "--force")
-        return json.loads((self.folder / "metrics.json").read_text())
 
 
 class Bytes(Case):
@@ -61,44 +43,6 @@ class Bytes(Case):
             self.assertRegex(c, r"^-?\d+\.\d{2}$")
             self.assertLessEqual(abs(float(a) - float(b)), 0.5000001e-4)
             self.assertLessEqual(abs(float(a) - float(c)), 0.5000001e-2)
-        self.assertIn("shortest", self.refused(2, "filter", log, "--method", "none", "--decimals", "many"))
-
-
-class Clock(Case):
-    def test_a_log_without_time_needs_a_rate(self):
-        text = "velocity_deg_s,torque_nm\n" + "90,3.5\n" * 500
-        log = self.write("log.csv", text)
-        self.assertIn("--sample-rate", self.refused(3, "filter", log, "--method", LOWPASS))
-        self.good("filter", log, "--method", LOWPASS, "--sample-rate", "1kHz")
-
-
-class Errors(Case):
-    good_rows = sine(300)
-
-    def broken(self):
-        lines = self.good_rows.splitlines(keepends=True)
-        swapped = lines[:100] + lines[150:151] + lines[100:]
-        yield "cut_line", "".join(lines[:-1]) + "0.3,9"
-        yield "text_in_number", self.good_rows.replace("0.120000,90.0", "0.120000,ninety")
-        yield "nan", self.good_rows.replace("0.120000,90.0", "0.120000,nan")
-        yield "wrong_column_count", self.good_rows.replace("0.120000,90.0", "0.120000,90.0,1,2")
-        yield "empty", ""
-        yield "only_header", lines[0]
-        yield "two_times", self.good_rows.replace("time_s,velocity_deg_s", "time_s,time_ms")
-        yield "backwards", "".join(swapped)
-        yield "wrong_unit", self.good_rows.replace("torque_nm", "torque [parsec]")
-        yield "binary", bytes(range(256)) * 40
-
-    def test_a_broken_log_gives_one_message_with_the_file_and_no_output(self):
-        for name, text in self.broken():
-            with self.subTest(name):
-                log = self.write(f"{name}.csv", text)
-                # A unit that nobody knows is asked for; everything else is refused.
-                code = 5 if name == "wrong_unit" else 3
-                message = self.refused(code, "filter", log, "--method", LOWPASS, "-o", "out.csv", "--metrics", "m.json")
-                self.assertIn(f"{name}.csv", message)
-                self.assertEqual(sorted(p.name for p in self.folder.iterdir() if not p.name.endswith(f"{name}.csv")), [])
-                log.unlink()
 
 
 class Threads(Case):

@@ -2,31 +2,15 @@
 """Several joints of a log in one pass: the same bytes as one joint after another."""
 
 import json
-import math
 
+from logs import three_joints
 from test_filter import Case
-
-ROWS = 6000
-
-
-def wide_log(rows=ROWS):
-    """Three joints whose speeds pass bands at different times, with ripple of their gears; j3 has no position."""
-    lines = ["time_s,j1_velocity_deg_s,j1_torque_nm,j1_position_deg,note,j2_torque_nm,j2_velocity_deg_s,j2_position_deg,"
-             "j3_velocity_deg_s,j3_torque_nm"]
-    position = [0.0, 0.0, 0.0]
-    for k in range(rows):
-        speed = [90 + 60 * math.sin(k / 400), 100 - 50 * math.cos(k / 700), -60 - 30 * math.sin(k / 300)]
-        torque = [1 + 0.5 * math.sin(math.radians(ratio * x)) for ratio, x in zip((100, 120, 80), position)]
-        lines.append(f"{k / 1000},{speed[0]:.4f},{torque[0]:.5f},{position[0]:.5f},run,{torque[1]:.5f},{speed[1]:.4f},"
-                     f"{position[1]:.5f},{speed[2]:.4f},{torque[2]:.5f}")
-        position = [x + v / 1000 for x, v in zip(position, speed)]
-    return "\n".join(lines) + "\n"
 
 
 class Joints(Case):
     def setUp(self):
         super().setUp()
-        self.log = self.write("wide.csv", wide_log())
+        self.log = self.write("wide.csv", three_joints())
         for joint, ratio in (("j1", 100), ("j2", 120), ("j3", 80)):
             self.good("design", "--gear-ratio", ratio, "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "20:180:20",
                       "--q", "1", "-o", f"{joint}.json")
@@ -48,7 +32,7 @@ class Joints(Case):
                 self.assertTrue(together != self.log.read_bytes(), "nothing was filtered")
 
     def test_any_number_of_threads_gives_the_same_bytes(self):
-        log = self.write("long.csv", wide_log(80_000))
+        log = self.write("long.csv", three_joints(80_000))
         self.assertGreater(log.stat().st_size, 6 << 20)  # threads start behind 4 MiB
         outputs = {self.good("filter", log, "--joint", "all", "--method", "switching,table={joint}.json", "--threads", threads).stdout
                    for threads in (1, 2, 3)}
@@ -87,7 +71,7 @@ class Joints(Case):
                     self.assertEqual(first.get(key), second.get(key), key)
 
     def test_motion_before_the_gears_is_divided_by_each_joints_own_ratio(self):
-        text = wide_log()
+        text = three_joints()
         head, *rows = (line.split(",") for line in text.splitlines())
         columns = [(head.index(f"{joint}_velocity_deg_s"), ratio) for joint, ratio in (("j1", 100), ("j2", 120), ("j3", 80))]
         for column, _ in columns:
@@ -106,23 +90,3 @@ class Joints(Case):
         torques = [[[float(c) for i, c in enumerate(line.split(",")) if head[i].endswith("torque_nm")]
                     for line in (self.folder / name).read_text().splitlines()[1:]] for name in ("motors_done.csv", "joints_done.csv")]
         self.assertLess(max(abs(a - b) for m, n in zip(*torques) for a, b in zip(m, n)), 1e-4)
-
-    def test_a_limit_that_one_joint_breaks_is_told_with_its_name(self):
-        done = self.run_tool("filter", self.log, "--joint", "all", "--method", "switching,table={joint}.json", "--max-delay", "12ms", "-o", "all.csv")
-        self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("joint j3: ", done.stderr.decode())
-
-    def test_what_needs_one_joint_says_so(self):
-        for words, said in ((("--json", "-o", "a.csv"), "{joint}"), (("--plot", "p.svg", "-o", "a.csv"), "--joint"),
-                            (("--metrics", "m.json", "-o", "a.csv"), "{joint}"),
-                            (("--columns", "torque=j1_torque_nm", "-o", "a.csv"), "--columns")):
-            with self.subTest(words[0]):
-                self.assertIn(said, self.refused(2, "filter", self.log, "--joint", "all", "--method", "switching,table=j1.json", *words))
-                self.assertFalse((self.folder / "a.csv").exists())
-        for joint in ("j1", "j2", "j3"):  # one that is missing leaves its joint out: test_all_joints.py
-            (self.folder / f"{joint}.json").unlink()
-        self.assertIn("j1.json", self.refused(4, "filter", self.log, "--joint", "all", "--method", "switching,table={joint}.json", "-o", "a.csv"))
-        self.assertFalse((self.folder / "a.csv").exists())
-        one = self.write("one.csv", "time_s,velocity_deg_s,torque_nm\n0,1,2\n0.001,1,3\n0.002,1,2\n")
-        self.assertIn("{joint}", self.refused(2, "filter", one, "--joint", "all", "--method", "switching,table={joint}.json"))
-        self.assertEqual(self.good("filter", one, "--joint", "all", "--method", "none").stdout, one.read_bytes())

@@ -109,23 +109,3 @@ class FrictionTable(Case):
         least = 0.95 * tables - 5.0 * math.sqrt(0.95 * 0.05 * tables)
         for key, count in hits.items():
             self.assertGreater(count, least, key)
-
-    def test_bad_tables_get_one_message(self):
-        head = "velocity_deg_s,torque_nm\n"
-        for text, words, code, message in (
-                (head + "1,0.6\n2,0.7\n", (), 3, "2 rows that move"),
-                (head + "5,0.6\n5,0.7\n-5,-0.6\n-5,-0.6\n", (), 3, "every row has the speed 5 deg/s"),
-                (head + "1,0.6\n2,broken\n3,0.7\n4,0.8\n", (), 3, "read 'broken'"),
-                (head + "1,-0.6\n2,-0.7\n3,-0.7\n4,-0.8\n", (), 3, "sign"),
-                (table(SPEEDS, random.Random(1)), ("--friction-table", "--validate", "table.csv"), 2, "--validate"),
-                (table(SPEEDS * 20, random.Random(1)), (), 3, "--friction-table"),
-                ("time_s,velocity_deg_s,torque_nm\n0,1,1\n1,2,1\n2,3,1\n3,4,1\n", ("--friction-table",), 3, "time")):
-            done = self.table(text, *words)
-            self.assertEqual((done.returncode, done.stdout), (code, ""), (text, done.stderr))
-            self.assertIn(message, done.stderr)
-            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-
-    def test_many_rows_are_a_table_where_that_is_said_and_a_stated_rate_makes_a_log(self):
-        text = table(both_ways(SPEEDS) * 10, random.Random(9))
-        self.assertEqual(self.found(text, "--friction-table")["rows"], 240)
-        ended(2, self.table(text, "--sample-rate", "1kHz"), "--model is missing")

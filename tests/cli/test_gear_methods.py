@@ -30,7 +30,3 @@ class Case(commands.Case):
     def setUp(self):
         super().setUp()
         (self.folder / "joint.json").write_text(joint())
-
-    def filtered(self, *words):
-        self.good("filter", MOVE, *words, "-o", "out.csv", "--metrics", "out.json", "--force")
-        return (self.folder / "out.csv").read_bytes(), json.loads((self.folder / "out.json").read_text())

@@ -154,25 +154,3 @@ class Plots(Case):
         fake.write_text("#!/bin/sh\nexit 127\n")
         fake.chmod(0o755)
         ended(4, self.plot(COMMANDS["spectrum"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin"), "no gnuplot")
-
-    def test_requests_that_make_no_sense_are_refused_before_any_work(self):
-        for words, part in ((["--plot", "picture.jpg"], ".svg"), (["--plot", "-", "--json"], "standard output")):
-            done = run(*COMMANDS["spectrum"], *words)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), words)
-            self.assertIn(part, done.stderr)
-        (self.folder / "mine.svg").write_text("mine")
-        done = run(*COMMANDS["spectrum"], "--plot", self.folder / "mine.svg")
-        self.assertEqual((done.returncode, done.stdout), (4, ""))
-        self.assertEqual((self.folder / "mine.svg").read_text(), "mine")
-
-    def test_a_result_does_not_know_of_its_picture(self):
-        plain, plotted = self.folder / "a.json", self.folder / "b.json"
-        run(*COMMANDS["candidate-table"], "-o", plain)
-        run(*COMMANDS["candidate-table"], "-o", plotted, "--plot", self.folder / "x.json")
-        self.assertEqual(plain.read_bytes(), plotted.read_bytes())
-
-    def test_the_filtered_log_is_the_same_with_and_without_a_picture(self):
-        words = ["filter", LOG, "--method", "lowpass,cutoff=13rad/s,order=1"]
-        run(*words, "-o", self.folder / "a.csv")
-        run(*words, "-o", self.folder / "b.csv", "--plot", self.folder / "x.json")
-        self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())

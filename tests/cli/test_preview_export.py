@@ -114,14 +114,3 @@ class PreviewIsExport(commands.Case):
         text = (self.folder / "track.h").read_text()
         self.assertIn("motor_speed_rpm", text)
         self.assertNotIn("speed_deg_s", text)
-
-    def test_what_would_run_otherwise_is_refused_with_what_runs(self):
-        for method, target, said in ((",transition=kep", "c-header", "none of parallel, keep-state-variable"),
-                                     ("", "c-header,form=df1", "transition=parallel"),
-                                     ("", "c-header,form=df2t", "transition=parallel"),
-                                     ("", "c-header,precision=q31", "range=200Nm"),
-                                     ("", "c-header,range=3Nm", "q31")):
-            done = self.run_tool("export", "--method", f"switching,table=table.json{method}", "--to", target)
-            self.assertEqual(done.returncode, 2, (method, target))
-            self.assertIn(said, done.stderr.decode())
-

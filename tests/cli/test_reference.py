@@ -79,19 +79,6 @@ class Reference(unittest.TestCase):
         for group in ("Look at a log:", "Filter it:", "Model the joint:", "Fleets:", "Report:"):
             self.assertIn("\n" + group, listed)
 
-    def test_what_people_type_elsewhere(self):
-        self.assertEqual(run("help", "identify").stdout, run("identify", "--help").stdout)
-        self.assertEqual(run("help").stdout, run("--help").stdout)
-        for words in (["-V"], ["version"]):
-            self.assertEqual(run(*words).stdout, run("--version").stdout)
-        self.assertEqual(run("help", "effects").stdout, run("diagnose", "--effects").stdout)
-        done = run("help", "nonsense")
-        self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("there is no command 'nonsense'", done.stderr)
-        done = run("--generate", "man-nonsense")
-        self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("expected one of man, man-COMMAND, complete-bash, catalogue", done.stderr)
-
 
 class Bash(Case):
     def completed(self, *words):

@@ -176,12 +176,3 @@ class Pages(SharedCase):
         with subprocess.Popen(["cp", DATA / "paper_60deg_s.csv", self.folder / "fifo"]):
             self.assertIn("<h1>fifo</h1>", self.page("fifo"))
         self.assertIn("record motion in one direction at several speeds", self.page("data/paper_rest.csv"))
-
-    def test_what_is_no_result_is_named(self):
-        for name, text in (("log.csv", "a,b\n1,2\n"), ("x.json", "{}"), ("y.json", '{"schema": "ripplenotch/joint/1"}')):
-            (self.folder / name).write_text(text)
-            done = run("report", name, cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (3, ""), name)
-            self.assertIn(name, done.stderr)
-        self.assertEqual(run("report").returncode, 2)
-        self.assertEqual(run("report", "nowhere.json", cwd=self.folder).returncode, 4)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The tool as a citizen of the shell: pipes, early ends, terminals, full disks, files that exist."""
+"""The tool as a citizen of the shell: signals, terminals, progress."""
 
-import json
 import os
 import pathlib
 import pty
@@ -24,54 +23,7 @@ def open_terminal():
         raise unittest.SkipTest(f"SKIPPED: there is no terminal here ({error})")
 
 
-def shell(command):
-    environment = dict(os.environ, PATH=f"{pathlib.Path(TOOL).parent}:{os.environ['PATH']}")
-    return subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, env=environment,
-                          stdin=subprocess.DEVNULL, timeout=60)
-
-
-class Provenance(Case):
-    def test_where_a_result_goes_and_how_much_is_told_is_no_part_of_its_command(self):
-        plain = f"ripplenotch info {LOG}"
-        target = self.folder / "info.json"
-        for words in (f"-o {target}", f"-o{target} -qv", f"-vqo {target}", f"-qo{target}", f"--output={target} -q -v",
-                      f"--output {target} --quiet --verbose --json"):
-            ended(0, shell(f"{plain} {words} --force"))
-            self.assertEqual(json.loads(target.read_text())["command"], plain, words)
-        done = shell(f"ripplenotch info --json -- {LOG} {LOG} -qv")
-        self.assertIn(b"-qv: ", done.stderr)  # behind -- it is a name
-        done = shell(f"ripplenotch info --json -v --columns -,velocity,torque --sample-rate 1kHz --no-header --skip-lines 1 {LOG}")
-        self.assertIn("--columns -,velocity,torque", json.loads(done.stdout)["command"])
-
-
 class Pipes(Case):
-    def test_a_log_flows_through_filter_into_spectrum(self):
-        done = ended(0, shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - | ripplenotch spectrum - --json"))
-        self.assertEqual(json.loads(done.stdout)["schema"], "ripplenotch/spectrum/1")
-
-    def test_a_pipe_and_a_file_give_the_same_bytes(self):
-        from_file = shell(f"ripplenotch filter --method {LOWPASS} {LOG}")
-        from_pipe = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} -")
-        dribbled = shell(f"dd if={LOG} bs=997 status=none | ripplenotch filter --method {LOWPASS} -")
-        self.assertEqual(from_file.returncode, 0, from_file.stderr)
-        self.assertEqual(from_file.stdout, from_pipe.stdout)
-        self.assertEqual(from_file.stdout, dribbled.stdout)
-
-    def test_a_binary_log_of_unknown_length_is_whole_in_a_pipe(self):
-        # Its header holds the number of rows, which a pipe of text tells only at its end.
-        target = self.folder / "out.npy"
-        self.assertEqual(shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}").returncode, 0)
-        piped = ended(0, shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - --output-format npy | cat"))
-        self.assertEqual(piped.stdout, target.read_bytes())
-        read = shell(f"cat {LOG} | ripplenotch filter --method none - --output-format npy | ripplenotch info - --json")
-        self.assertEqual(json.loads(read.stdout)["rows"], 4000)
-
-    def test_a_reader_that_leaves_early_ends_the_tool_quietly(self):
-        done = shell(f"(for i in $(seq 200); do tail -n +2 {LOG} | cut -d, -f2-; done) "
-                     f"| ripplenotch filter --columns velocity,torque,position --no-header --sample-rate 1kHz -q "
-                     f"--method {LOWPASS} - | head -n 2; test ${{PIPESTATUS[2]}} -eq 0")
-        self.assertEqual(done.stderr, b"")
-        self.assertEqual(len(done.stdout.splitlines()), 2)
 
     def has_begun(self, tool, folder):
         """Whether the tool has a file in the folder, with or without a name."""
@@ -112,9 +64,6 @@ class Pipes(Case):
 
     def test_an_ignored_signal_stays_ignored(self):
         self.assertEqual(self.interrupted(self.folder, signal.SIGHUP, ignored=True), (0, ["out.csv"]))
-
-    def test_a_full_disk_is_exit_code_4_with_a_reason(self):
-        ended(4, shell(f"ripplenotch filter --method {LOWPASS} {LOG} > /dev/full"), b"No space left")
 
 
 class Terminals(unittest.TestCase):
@@ -179,18 +128,3 @@ class Progress(Case):
         self.assertEqual(self.slow([], terminal=False), (0, ""))
         self.assertEqual(self.slow(["-q"]), (0, ""))
         self.assertEqual(self.slow([], seconds=0.0), (0, ""))
-
-
-class Files(Case):
-    def test_nothing_is_overwritten_unasked(self):
-        target = self.folder / "out.csv"
-        target.write_text("mine")
-        command = f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}"
-        ended(4, shell(command), b"--force")
-        self.assertEqual(target.read_text(), "mine")
-        self.assertEqual(shell(command + " --force").returncode, 0)
-        self.assertNotEqual(target.read_text(), "mine")
-        self.assertEqual(os.listdir(self.folder), ["out.csv"])
-
-    def test_a_folder_that_cannot_be_written_is_exit_code_4(self):
-        ended(4, shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o /proc/none/out.csv"), b"/proc/none/out.csv")

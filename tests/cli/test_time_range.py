@@ -4,7 +4,7 @@
 import json
 import math
 
-from commands import ACCOUNTS, DATA, Case, asked_for_json, ended
+from commands import ACCOUNTS, DATA, Case, asked_for_json
 
 METHOD = ["--method", "tracking,gear-ratio=100,orders=1:2"]
 
@@ -50,9 +50,6 @@ class TwoLogs(Case):
     def write(self, side, lines, name="log.csv", end="\n"):
         (self.folder / side / name).write_bytes(end.join([*lines, ""]).encode())
 
-    def run_in(self, side, *words, **more):
-        return self.run_tool(*words, cwd=self.folder / side, **more)
-
     def said(self, side, *words, **more):
         return self.good(*words, cwd=self.folder / side, **more).stdout
 
@@ -97,16 +94,6 @@ class Law(TwoLogs):
             text = self.said("whole", words[0], "--help-all").decode()
             for option in ("--from TIME", "--to TIME"):
                 self.assertIn(option, text, name)
-
-    def test_one_end_is_enough_and_both_ends_belong(self):
-        rows = [plain(*row) for row in motion(1000)]
-        self.write("whole", [HEAD, *rows])
-        for limits, kept in ((["--from", "0.2"], rows[200:]), (["--to", "0.7s"], rows[:701]),
-                             (["--from", "0.1999", "--to", "700.9ms"], rows[200:701]), (["--from", "0"], rows),
-                             (["--from", "0.998", "--to", "0:00.999"], rows[998:])):
-            with self.subTest(limits):
-                written = self.said("whole", "filter", "log.csv", "--method", "none", *limits)
-                self.assertEqual(written.decode().splitlines(), [HEAD, *kept])
 
     def test_stamps_in_another_unit_are_met_exactly(self):
         rows = [f"{1000 + k};{1 + k % 3},5;{k},25" for k in range(3000)]
@@ -210,63 +197,3 @@ class Clocks(TwoLogs):
         self.log_of_stamps(lambda k: k % 13, "note")
         outside = self.info_and_filter(["--from", "1.5", "--to", "2.5"], read=["--sample-rate", "1kHz"])
         self.assertEqual((outside["before"], outside["after"], outside["zero_s"]), (1500, 1499, 1.5))
-
-
-class Words(TwoLogs):
-    def setUp(self):
-        super().setUp()
-        self.rows = [plain(*row) for row in motion(1000)]
-        self.write("whole", [HEAD, *self.rows])
-
-    def refused(self, code, *words, side="whole"):
-        done = ended(code, self.run_in(side, *words))
-        self.assertEqual(done.stdout, b"")
-        message = done.stderr.decode()
-        self.assertEqual(message.count("\n"), 1, message)
-        return message
-
-    def test_ranges_that_keep_nothing_are_refused_in_one_line(self):
-        for limits, said in ((["--from", "5", "--to", "7"], ("--from 5 --to 7 keeps no row", "covers 0 s to 0.999 s in 1000 rows")),
-                             (["--from", "5"], ("--from 5 keeps no row",)),
-                             (["--from", "0.9985"], ("keeps one row only", "0.999 s")),
-                             (["--from", "0.5003", "--to", "0.5004"], ("keeps no row",)),
-                             (["--from", "2:00", "--to", "0.5"], ("ends at 0.5 s, before it begins at 120 s", "swap")),
-                             (["--from", "-1"], ("--from -1 is below 0 s", "begins at 0 s")),
-                             (["--to", "-500ms"], ("--to -500ms is below 0 s", "begins at 0 s")),
-                             (["--from", "2024-05-01T12:30:00"], ("no date", "write seconds"))):
-            for command in (["info", "log.csv"], ["filter", "log.csv", *METHOD], ["spectrum", "log.csv", "--segment", "0.1s"]):
-                with self.subTest(limits=limits, command=command[0]):
-                    message = self.refused(2, *command, *limits)
-                    for part in ("log.csv", *said):
-                        self.assertIn(part, message)
-        self.assertFalse((self.folder / "whole" / "out.csv").exists())
-
-    def test_what_is_no_time_is_refused(self):
-        for text in ("12:3", "1:60", "1:2:3", "x", "5Hz", "1:30s", ":30", "1:30:", "12:30:00:00"):
-            with self.subTest(text):
-                self.assertIn("--from", self.refused(2, "info", "log.csv", "--from", text))
-        self.assertIn("no LOG", self.refused(2, "compare", "--step", "10Nm", "--sample-rate", "1kHz", "--from", "1"))
-        self.write("whole", ["velocity_deg_s,torque_nm", "1,2", "1,3", "1,2"], "untimed.csv")
-        self.assertIn("--sample-rate", self.refused(3, "info", "untimed.csv", "--from", "1"))
-
-    def test_negative_times_are_taken_where_the_log_has_them(self):
-        rows = [f"{(k - 500) / 1000},{k % 7},{k % 5}" for k in range(1000)]
-        self.write("whole", ["time_s,velocity_deg_s,torque_nm", *rows])
-        written = self.said("whole", "filter", "log.csv", "--method", "none", "--from", "-0.25", "--to=-100ms")
-        self.assertEqual(written.decode().splitlines()[1:], rows[250:401])
-
-    def test_a_broken_row_inside_is_told_by_its_line_in_the_file(self):
-        self.write("whole", [HEAD, "# remark", *self.rows[:600], "0.6,1,oops,3", *self.rows[600:]])
-        message = self.refused(3, "filter", "log.csv", *METHOD, "--from", "0.4", "-o", "out.csv")
-        self.assertIn("log.csv:603:7: read 'oops'", message)
-        self.write("whole", [HEAD, *self.rows[:600], "zero,1,2,3", *self.rows[600:]])
-        self.assertIn("log.csv:602:1: read 'zero'", self.refused(3, "info", "log.csv", "--from", "0.4"))
-        self.said("whole", "info", "log.csv", "--from", "0.6")
-
-    def test_nothing_is_dropped_without_a_word(self):
-        text = self.said("whole", "info", "log.csv", "--from", "0.2", "--to", "0.7").decode()
-        self.assertIn("range     only rows from 0.2 s to 0.7 s; left out are 200 rows before and 299 after", text)
-        self.assertIn("log.csv: 501 rows over 0.5 s", text)
-        done = self.run_in("whole", "filter", "log.csv", *METHOD, "-o", "out.csv", "-v", "--from", "0.2")
-        self.assertIn("200 rows before and 0 after are left out, by --from and --to", done.stderr.decode())
-        self.assertNotIn("rows_outside", self.said("whole", "info", "log.csv", "--json").decode())

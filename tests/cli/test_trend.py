@@ -26,14 +26,6 @@ class Case(commands.Case):
         done = ended(0, trend("-", "--json", *words, text=text_of(lines)))
         return json.loads(done.stdout)
 
-    def refused(self, lines, *words):
-        done = trend("-", text=text_of(lines))
-        self.assertEqual((done.returncode, done.stdout), (3, ""))
-        said = [line for line in done.stderr.splitlines() if "warning" not in line]
-        self.assertEqual(len(said), 1, done.stderr)
-        for word in words:
-            self.assertIn(word, said[0])
-
 
 def lines_of(made):
     return [line for joint in made for line in joint.lines]
@@ -182,25 +174,6 @@ class BadInput(Case):
     def setUp(self):
         super().setUp()
         self.lines = lines_of(fleet.fleet(2, 30, 41, events=False))
-
-    def test_each_is_one_clear_line(self):
-        self.refused([], "no lines")
-        self.refused(self.lines[:1], "one log only")
-        self.refused([{**line, "version": "9.9"} if i == 3 else line for i, line in enumerate(self.lines)], "two versions", "9.9")
-        self.refused([{**line, "date": "2026-01-01T00:00:00Z"} for line in self.lines], "2026-01-01", "different days")
-        self.refused([{**line, "date": None, "not_told": {**line["not_told"], "date": "no day"}} for line in self.lines], "no line has a date")
-        self.refused([{("coulomb_friction_mnm" if name == "coulomb_friction_nm" else name): value for name, value in line.items()}
-                      for line in self.lines], "line 1", "coulomb_friction_mnm", "coulomb_friction_nm")
-
-    def test_broken_lines_are_named_with_their_number(self):
-        for field, value in (("rows", "many"), ("gear_ratio", "x"), ("gear_ratio_ci95", [2, 1]), ("date", "soon"), ("schema", "x/1"),
-                             ("inertia_kgm2", None), ("no_such_thing", 1)):
-            lines = [dict(line) for line in self.lines]
-            lines[2][field] = value
-            lines[2]["not_told"] = {}
-            for name in [name for name, had in lines[2].items() if had is None and name != field]:
-                lines[2]["not_told"][name] = "reason"
-            self.refused(lines, "line 3", field)
 
     def test_few_logs_of_a_joint_are_a_note(self):
         told = self.trend(self.lines[:5] + self.lines[-12:])

@@ -138,3 +138,34 @@ def two_links(seed, coulomb_nm=0.0, seconds=30.0, rate=250.0, sign=(1, 1), delay
             cells += [f"{math.degrees(q):.6f}", f"{math.degrees(v) + noise.gauss(0.0, 0.02):.5f}", f"{torque:.5f}"]
         lines.append(",".join(cells))
     return "\n".join(lines) + "\n"
+
+
+def wide(joints, rows=4000, without=()):
+    """Joints that move through all speeds, each with ripple of its own. `without`: columns that are not there."""
+    names = [[f"{joint}_{name}" for name in ("velocity_deg_s", "torque_nm", "position_deg")] for joint in joints]
+    lines = ["time_s," + ",".join(name for columns in names for name in columns if name not in without)]
+    position = [0.0] * len(joints)
+    for k in range(rows):
+        cells = [f"{k / 1000:.3f}"]
+        for j, columns in enumerate(names):
+            speed = 90 + 60 * math.sin(k / 500 + j)
+            ripple = 0.5 / (j + 1) * math.cos(math.radians(100 * position[j])) + 0.2 * math.cos(math.radians(200 * position[j]))
+            values = speed, 3 * math.sin(k / 900) + ripple + 0.02 * math.sin(7.3 * k * k + j), position[j]
+            cells += [f"{value:.5f}" for name, value in zip(columns, values) if name not in without]
+            position[j] += speed / 1000
+        lines.append(",".join(cells))
+    return "\n".join(lines) + "\n"
+
+
+def three_joints(rows=6000):
+    """Joints whose speeds pass bands at different times, with ripple of their gears; j3 has no position."""
+    lines = ["time_s,j1_velocity_deg_s,j1_torque_nm,j1_position_deg,note,j2_torque_nm,j2_velocity_deg_s,j2_position_deg,"
+             "j3_velocity_deg_s,j3_torque_nm"]
+    position = [0.0, 0.0, 0.0]
+    for k in range(rows):
+        speed = [90 + 60 * math.sin(k / 400), 100 - 50 * math.cos(k / 700), -60 - 30 * math.sin(k / 300)]
+        torque = [1 + 0.5 * math.sin(math.radians(ratio * x)) for ratio, x in zip((100, 120, 80), position)]
+        lines.append(f"{k / 1000},{speed[0]:.4f},{torque[0]:.5f},{position[0]:.5f},run,{torque[1]:.5f},{speed[1]:.4f},"
+                     f"{position[1]:.5f},{speed[2]:.4f},{torque[2]:.5f}")
+        position = [x + v / 1000 for x, v in zip(position, speed)]
+    return "\n".join(lines) + "\n"
