@@ -446,7 +446,7 @@ struct Search {
 // One step from here: the first of successively shorter ones that lowers the sum of squares. Returns false
 // when none does. Linear values are solved for anew where the others come to (variable projection: Golub and
 // Pereyra, 1973): of the 54 starts of NIST's problems 53 lead to the certified values with it, 46 without it
-// (tests/model/strd_test.cpp).
+// (tests/model/fit_test.cpp).
 bool step_down(const Problem& problem, Search& search, const std::vector<std::size_t>& moving,
                double& damping) {
     const Factored factored = factor(problem.slopes(search.place, moving), search.place.residual);

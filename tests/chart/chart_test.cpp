@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Figures of rare results; those of the documentation are compared with their data by
-// tests/cli/test_figures.py.
+// tests/cli/test_documented.py.
 #include <algorithm>
 #include <cmath>
 

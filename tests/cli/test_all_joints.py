@@ -131,19 +131,3 @@ class Currents(Case):
         amps = self.good("spectrum", "amps.csv", "--joint", "j1", "-q").stdout
         newton_metres = self.good("spectrum", "amps.csv", "--joint", "j1", "-q", "--kt", "1").stdout
         self.assertEqual([len(line) for line in amps.splitlines()[1:3]], [len(line) for line in newton_metres.splitlines()[1:3]])
-
-
-class Columns(Case):
-    def test_every_column_of_a_file_is_listed_with_what_it_was_taken_for(self):
-        names = ["time_s", "j1_velocity_deg_s", "j1_torque_nm", "j1_target_torque_nm", "j2_torque_percent", "temperature_degc"]
-        names += [f"note_{k}" for k in range(20)]
-        rows = [",".join([f"{k / 100}", "90", f"{k % 7}", "1", "3"] + ["20"] * 21) for k in range(300)]
-        (self.folder / "log.csv").write_text("\n".join([",".join(names), *rows]) + "\n")
-        self.assertIn("other columns", self.good("info", "log.csv").stdout)
-        listed = self.good("info", "log.csv", "-v").stdout
-        for name in names:
-            self.assertIn(name, listed)
-        for name, said in (("time_s", "time"), ("j1_torque_nm", "torque"), ("j1_target_torque_nm", "not used: a torque that is a wish"),
-                           ("temperature_degc", "not used: its name"), ("note_19", "not used: its name")):
-            self.assertRegex(listed, rf"(?m)^ +\d+  {name} +{said}")
-        self.assertRegex(listed, r"(?m)^ +\d+  j2_torque_percent +not used: ")

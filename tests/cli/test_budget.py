@@ -4,7 +4,7 @@
 import json
 import math
 
-from commands import SharedCase, good, run
+from commands import SharedCase, good
 from logs import two_lines
 
 RIPPLE_NM = (0.8, 0.5)
@@ -138,11 +138,3 @@ class LowSpeed(Budget):
                        "tracking,gear-ratio=100,orders=1:2,low=park", "lowpass,cutoff=3Hz,order=2"):
             self.assertGreater(left_nm(method), 0.4 * raw, method)
         self.assertLess(left_nm("oscillator,gear-ratio=100,orders=1:2"), 0.08 * raw)
-
-    def test_design_names_the_speed_below_which_no_notch_keeps_the_delay(self):
-        words = ["design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--max-delay", "20ms"]
-        text = self.good(*words, "--speed", "18:180").stdout
-        speed = float(text.split("Below ")[1].split(" deg/s")[0])
-        self.assertAlmostEqual(speed, 3.6 * 1.5 / (2 * math.pi * 5 * 0.020), delta=0.01)
-        self.assertEqual(run(*words, "--speed", f"{0.98 * speed:.4f}:180", cwd=self.folder).returncode, 1)
-        self.assertEqual(run(*words, "--speed", f"{1.02 * speed:.4f}:180", cwd=self.folder).returncode, 0)

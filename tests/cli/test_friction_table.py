@@ -74,23 +74,6 @@ class FrictionTable(Case):
                         low, high = value["ci95"]
                         self.assertLess(abs(value["value"] - viscous_difference), high - low)
 
-    def test_without_slow_rows_or_with_one_direction_that_is_said(self):
-        fast = self.found(table(both_ways([60, 70, 80, 90]), random.Random(7)))
-        self.assertIn("stribeck-friction", [one["effect"] for one in fast["undecidable"]])
-        one_way = self.found(table(SPEEDS, random.Random(8)))
-        names = [one["effect"] for one in one_way["undecidable"]]
-        self.assertIn("asymmetric-friction", names)
-        self.assertIn("asymmetric-viscous-friction", names)
-        self.assertIn("offset", names)
-
-    def test_units_of_the_header_count_and_rows_at_rest_do_not(self):
-        rows = "".join(f"{math.radians(v):.8f},{1e3 * friction(v):.4f}\n" for v in both_ways(SPEEDS))
-        found = self.found("velocity_rad_s,torque_mNm\n" + rows + "0,12\n")
-        self.assertEqual(found["rows_at_rest"], 1)
-        values = self.parameters(found)
-        self.assertAlmostEqual(values["coulomb-friction", "torque_nm"]["value"], 0.6, delta=1e-4)
-        self.assertAlmostEqual(values["viscous-friction", "coefficient_nm_per_deg_s"]["value"], 0.01, delta=1e-5)
-
     def test_intervals_hold_the_truth_as_often_as_they_say(self):
         # RIPPLENOTCH_TABLES=500 RIPPLENOTCH_FIRST_TABLE=9000 is the study of docs/studies/friction-table.md.
         tables, first = int(os.environ.get("RIPPLENOTCH_TABLES", "60")), int(os.environ.get("RIPPLENOTCH_FIRST_TABLE", "1"))

@@ -6,7 +6,7 @@ import math
 import random
 import unittest
 
-from commands import LOGS, Case, ended, run
+from commands import LOGS, ended, run, Case
 from logs import steady
 
 
@@ -152,30 +152,6 @@ class Doubts(Case):
         self.assertIn("2 times mains 50 Hz", notes)
         self.assertNotIn("mains 60 Hz", notes)
 
-    def test_the_family_without_the_position(self):
-        logs = [self.log(f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, position=False, seed=v)
-                for v in (36, 48)]
-        found = identified(*logs)
-        # Of one size at 30 Hz, and at 40 Hz at a speed higher by a third: an order there would leave the 30 Hz of one log and the 40 Hz of
-        # the other to two tones, which explain all four.
-        self.assertEqual(orders(found), [])
-        self.assertIsNone(found["gear_ratio"]["value"])
-        self.assertEqual(sorted(round(line["hz"], -1) for line in found["lines"]), [20, 30, 40, 50])
-
-    def test_a_joint_that_wears_is_told_log_by_log(self):
-        wear = (0.38, 0.52, 0.74, 0.96)
-        logs = [self.log(f"{i}_{v}.csv", speed=v, ripple_nm=nm, seed=10 * i + v)
-                for i, nm in enumerate(wear) for v in (40, 70)]
-        done = run("identify", *logs, "-q")
-        self.assertIn("The recordings disagree", done.stdout.splitlines()[0])
-        self.assertIn("0_40.csv", done.stdout)
-        one = identified(*logs)["disagreements"][0]
-        self.assertEqual(one["about"], "amplitude")
-        values = [value["value"] for value in one["values"]]
-        self.assertEqual(len(values), len(wear))
-        for value, nm in zip(values, wear):
-            self.assertAlmostEqual(value, nm, delta=0.05 * nm)
-
 
 @unittest.skipUnless((LOGS / "README.md").is_file(), "the real logs are not here")
 class RealLogs(unittest.TestCase):
@@ -188,3 +164,24 @@ class RealLogs(unittest.TestCase):
                     self.assertIsNotNone(found["gear_ratio"]["value"], (joint, words, hint))
                     self.assertAlmostEqual(found["gear_ratio"]["value"], ratio, delta=0.003 * ratio)
                     self.assertIn(8, [line["order"] for line in found["lines"]])
+
+
+# identify on logs in the layouts that people have, whose truth is known: ../shared/cases-4, section 2. Gear 100 where nothing.
+# else is said, order 1 of 0.8 Nm and order 2 of 0.5 Nm zero to peak.
+CASES = LOGS.parent / "cases-4"
+
+
+@unittest.skipUnless(CASES.is_dir(), "no logs of ../shared/cases-4")
+class CasesOfUsers(Case):
+    def answered(self, name, *words):
+        done = self.run_tool("identify", "--json", "-q", CASES / f"{name}.csv.gz", *words)
+        self.assertIn(done.returncode, (0, 5), done.stderr)
+        return json.loads(done.stdout)
+
+    @unittest.expectedFailure  # A line whose amplitude changes within a sweep by more than 40 % is lost.
+    def test_an_amplitude_that_grows_with_speed(self):
+        found = self.answered("ripple_grows_with_speed")
+        for order in (100.0, 200.0):
+            self.assertTrue(any(abs((line["order_output"] or 0.0) / order - 1.0) <= 0.01 for line in found["lines"]), found["verdict"])
+        if found["conclusive"]:
+            self.assertAlmostEqual(found["gear_ratio"]["value"], 100.0, delta=1.0)

@@ -14,8 +14,7 @@ import shlex
 import struct
 import unittest
 
-from commands import LOGS, TOOL, Case, ended, run, sanitized
-
+from commands import LOGS, TOOL, ended, run, sanitized, Case
 
 RATIO, RATE = 100.0, 500.0
 EPOCH_NS = 1_700_000_000_123_456_789
@@ -334,18 +333,6 @@ class ChannelsWithClocksOfTheirOwn(unittest.TestCase):
 
 
 class WhatIsSaidWithoutAUnit(Case):
-    def test_the_first_sentence_says_that_nothing_is_told_and_quiet_does_not_hide_it(self):
-        (self.folder / "log.csv").write_bytes(DIALECTS["plain words"][0])
-        done = self.run_tool("identify", "log.csv", "-q")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertTrue(done.stdout.startswith("Cannot tell: the log does not state its units"), done.stdout)
-        self.assertIn("note: if it is rad/s and rad, as assumed: Ripple", done.stdout)
-        self.assertIn("note: if the speed is in deg/s (", done.stdout)
-        self.assertEqual(self.run_tool("identify", "log.csv", "--require-conclusive").returncode, 5)
-        found = json.loads(self.run_tool("identify", "log.csv", "--json", "-q").stdout)
-        self.assertFalse(found["conclusive"])
-        self.assertIsNone(found["gear_ratio"]["value"])
-        self.assertEqual(found["recording"]["assumptions"][0]["settle_with"], "--unit velocity=rad/s,position=rad")
 
     def test_info_and_filter_read_the_same_units(self):
         for name in ("plain words", "motor velocity by position", "timestamp in ns", "ROS 2, sec and nanosec"):
@@ -367,12 +354,6 @@ class WhatIsSaidWithoutAUnit(Case):
         found = json.loads(self.run_tool("identify", "log.csv", "--json", "-q").stdout)
         self.assertTrue(found["verdict"].startswith("Cannot tell the gear ratio: "), found["verdict"])
         self.assertEqual(sorted(round(line["order"]) for line in found["lines"]), [1, 2])
-
-    def test_lines_above_a_table_can_be_skipped_and_stay_in_what_is_written(self):
-        text = table("time_s|velocity_deg_s|torque_nm", "t|deg/s|Nm").decode()
-        (self.folder / "log.csv").write_text("run 7, warm, 0.5\nsecond line, 1, 2\n" + text)
-        ended(0, self.run_tool("filter", "log.csv", "--skip-lines", "2", "--method", "none", "-o", "out.csv", "-q"))
-        self.assertTrue((self.folder / "out.csv").read_text().startswith("run 7, warm, 0.5\nsecond line, 1, 2\ntime_s,"))
 
     @unittest.skipIf(sanitized(TOOL), "sanitizers need address space of their own")
     def test_a_clock_in_a_wrong_unit_makes_no_memory_grow(self):
@@ -466,16 +447,6 @@ class OtherShapes(Case):
         ended(0, self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv", "-q"))
         self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_s,velocity_deg_s,torque_nm,position_deg")
 
-    def test_electrical_speed_asks_for_the_pairs_of_poles(self):
-        poles = 7
-        rows = "".join(f"{r.t:.4f};{r.velocity * RATIO / 6 * poles:.4f};{r.torque:.4f}\n" for r in ROWS)
-        (self.folder / "log.csv").write_text("time_s;erpm;torque_nm\n" + rows)
-        words = ["identify", "log.csv", "--gear-ratio", str(RATIO), "--json", "-q"]
-        done = self.run_tool(*words)
-        self.assertEqual((done.returncode, "--scale velocity=1rpm/7 for 7 pole pairs" in done.stderr), (5, True), done.stderr)
-        done = self.run_tool(*words, "--scale", f"velocity=1rpm/{poles}")
-        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
-
     def test_a_linear_axis_asks_for_its_lead_and_is_then_that_of_its_screw(self):
         lead_m = 0.005
         rows = [(r.t, r.position * lead_m / 360, r.velocity * lead_m / 360, r.torque * 2 * math.pi / lead_m) for r in ROWS]
@@ -501,22 +472,68 @@ class OtherShapes(Case):
         (self.folder / "motor.csv").write_text("t_s,q_m,dq_m,tau_m\n" + of_the_screw)
         self.assertNotIn("lead", self.run_tool("identify", "motor.csv", *words).stderr)
 
-    def test_symbols_with_a_ratio_name_the_other_reading_wherever_they_are_read(self):
-        rows = "".join(f"{r.t:.4f},{r.velocity:.6f},{r.torque:.4f},{r.position:.6f}\n" for r in ROWS)
-        (self.folder / "log.csv").write_text("t,v,tau,q\n" + rows)
-        done = self.run_tool("filter", "log.csv", "--gear-ratio", str(RATIO), "--method", "lowpass,cutoff=20Hz", "-o", "out.csv")
-        self.assertIn("warning: no unit is stated for what is read: took 'v'", done.stderr)
-        done = self.run_tool("identify", "log.csv", "--gear-ratio", str(RATIO))
-        self.assertTrue(done.stdout.startswith("Cannot tell: the log does not state its units"), done.stdout)
-        self.assertIn("--unit velocity=deg/s --side joint", done.stdout)
 
-    def test_joints_paired_one_off_are_refused_and_listed_by_info(self):
-        header = "time_s," + ",".join(f"q{k}" for k in range(3)) + "," + ",".join(f"tau{k + 1}" for k in range(3))
-        rows = "".join(f"{r.t:.4f}," + ",".join([f"{r.position * DEG:.6f}"] * 3 + [f"{r.torque:.4f}"] * 3) + "\n" for r in ROWS)
-        (self.folder / "log.csv").write_text(header + "\n" + rows)
-        for joint in ([], ["--joint", "1"], ["--joint", "all"]):
-            done = self.run_tool("identify", "log.csv", *joint)
-            self.assertEqual((done.returncode, "--columns torque=tau1,position=q0" in done.stderr), (3, True), done.stderr)
-        self.assertIn("numbered from 1 and from 0", self.run_tool("info", "log.csv").stdout)
-        done = self.run_tool("identify", "log.csv", "--columns", "torque=tau3,position=q2", "--json", "-q")
-        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
+# Clocks that a file or its reader states: the step in the head of a .lvm, and counters whose unit the user says.
+
+def lvm_without_times(x_value=True, step="0.002", dimension="Time"):
+    """X_Columns No: the cells of X_Value are empty, or there is no such column, and Delta_X is the clock."""
+    head = lvm().decode()
+    head = head[:head.index("X_Value")].replace("X_Columns\tOne", "X_Columns\tNo")
+    head = head.replace("0.002\t0.002\t0.002", "\t".join([step] * 3)).replace("Time\tTime\tTime", "\t".join([dimension] * 3))
+    names, columns = ("X_Value|", "|") if x_value else ("", "")
+    return table(f"{names}velocity|torque|position|Comment", f"{columns}deg/s|Nm|deg", delimiter="\t", head=head)
+
+
+class Clocks(Case):
+    def recording(self, content, *options):
+        (self.folder / "log.csv").write_bytes(content)
+        done = ended(0, self.run_tool("identify", "log.csv", "--json", "-q", *options))
+        found = json.loads(done.stdout)
+        return found["recording"], found["gear_ratio"]["value"]
+
+
+class LabView(Clocks):
+    def test_the_head_is_the_clock_of_a_file_without_one(self):
+        for x_value in (True, False):
+            with self.subTest(x_value=x_value):
+                recording, ratio = self.recording(lvm_without_times(x_value), "--unit", "velocity=deg/s,position=deg")
+                self.assertEqual((recording["nominal_rate_hz"], recording["rate_stated"], recording["gap_count"]), (500, True, 0))
+                self.assertAlmostEqual(ratio, 100, delta=0.5)
+                told = [one for one in recording["inferences"] if one["about"] == "time"]
+                self.assertEqual([(one["assumed"], one["settle_with"]) for one in told], [("0.002 s a row", "--sample-rate 500Hz")])
+
+    def test_every_row_is_as_far_from_the_last_in_what_is_written(self):
+        (self.folder / "log.csv").write_bytes(lvm_without_times(step="0.004"))
+        self.assertEqual(self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.npy", "-q").returncode, 0)
+        seen = json.loads(self.run_tool("info", "out.npy", "--json").stdout)
+        self.assertEqual((seen["sample_rate_hz"], seen["rows"]), (250, len(ROWS)))
+
+    def test_times_and_options_come_before_the_head(self):
+        content = lvm().replace(b"Delta_X\t0.002\t0.002\t0.002", b"Delta_X\t0.004\t0.004\t0.004")
+        self.assertEqual(self.recording(content)[0]["nominal_rate_hz"], 500)
+        self.assertEqual(self.recording(lvm_without_times(step="0.004"), "--sample-rate", "500Hz")[0]["nominal_rate_hz"], 500)
+
+    def test_a_step_that_is_no_time_or_differs_by_channel_is_none(self):
+        for content in (lvm_without_times(dimension="Frequency"), lvm_without_times(step="0.0"),
+                        lvm_without_times().replace(b"0.002\t0.002\t0.002", b"0.002\t0.004\t0.002")):
+            (self.folder / "log.csv").write_bytes(content)
+            done = self.run_tool("identify", "log.csv", "-q")
+            self.assertEqual(done.returncode, 3, done.stdout)
+
+
+class Counters(Clocks):
+    """libfranka counts milliseconds, one a row: a row number, until somebody says what it counts."""
+
+    def libfranka(self, name):
+        rows = "".join(f"{5000 + r.k},{math.radians(r.velocity):.7f},{r.torque:.5f},{math.radians(r.position):.8f}\n" for r in ROWS)
+        return f"{name},dq,tau_J,q\n{rows}".encode()
+
+    def test_a_stated_unit_is_believed(self):
+        for name, options in (("time", ["--unit", "time=ms"]), ("t", ["--unit", "t=ms"]), ("timestamp", ["--unit", "time=ms"]),
+                              ("count", ["--columns", "time=count", "--unit", "time=ms"])):
+            with self.subTest(name=name, options=options):
+                self.assertEqual(self.recording(self.libfranka(name), *options)[0]["nominal_rate_hz"], 1000)
+
+    def test_without_one_the_option_is_named(self):
+        (self.folder / "log.csv").write_bytes(self.libfranka("time"))
+        ended(3, self.run_tool("identify", "log.csv"), "--unit time=ms")

@@ -94,8 +94,8 @@ class Compensators(Case):
         self.map.write_text(json.dumps(found))
         named = self.folder / "named.csv"
         named.write_text(self.log.read_text().replace("velocity_deg_s,torque_nm,position_deg", "j3_velocity_deg_s,j3_torque_nm,j3_position_deg", 1))
-        ended(2, run("filter", named, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv"),
-              "the map is of joint j4, and the log is of joint j3")
+        for command in ("filter", named, "-o", self.folder / "z.csv"), ("compare", named):
+            ended(2, run(*command, "--method", f"map,map={self.map}"), "the map is of joint j4, and the log is of joint j3")
         found["joint"], found["range"]["speed_deg_s"] = "", [1.0, 40.0]
         self.map.write_text(json.dumps(found))
         for command in ("filter", self.log, "-o", self.folder / "fast.csv"), ("compare", self.log):
@@ -105,15 +105,6 @@ class Compensators(Case):
                 self.assertFalse((self.folder / "fast.csv").exists())
         ended(0, run("filter", self.log, "--method", f"map,map={self.map},beyond=hold", "-o", self.folder / "z.csv", "--force"),
               "its map was made at 1 to 40 deg/s")
-
-    def test_compare_names_the_joint_of_another_map_too(self):
-        write_log(self.log, 1)
-        found, _ = self.made(self.log)
-        found["joint"] = "j4"
-        self.map.write_text(json.dumps(found))
-        named = self.folder / "named.csv"
-        named.write_text(self.log.read_text().replace("velocity_deg_s,torque_nm,position_deg", "j3_velocity_deg_s,j3_torque_nm,j3_position_deg", 1))
-        ended(2, run("compare", named, "--method", f"map,map={self.map}"), "the map is of joint j4, and the log is of joint j3")
 
     def test_against_the_true_torque_a_map_leaves_the_noise(self):
         write_log(self.log, 1)

@@ -162,13 +162,6 @@ class Clocks(Account):
         self.assertAlmostEqual(account["rate_changes"][0]["to_hz"], 167, delta=0.01)
         self.assertTrue(any("data row 17001" in warning for warning in info["warnings"]))
 
-    def test_a_clock_of_no_use_is_summed_up_without_a_rate(self):
-        log = self.folder / "coarse.csv"
-        log.write_text("time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k // 10 * 0.01:.2f},30,{k % 7}\n" for k in range(3000)))
-        said = run("info", log).stdout
-        self.assertIn(" filter       no   time advances once in 10 rows", said)
-        self.assertRegex(said.split("\n")[0], r": 3000 rows over [0-9.]+ s, speed 30 to 30 deg/s")
-
     def test_rows_at_another_rate_pass_as_they_are(self):
         log, out = self.hard["rate_falls_on_the_way"], self.folder / "passed.csv"
         ended(0, run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", out, "--force"))

@@ -6,7 +6,7 @@ import math
 import unittest
 
 from commands import DATA, LOGS, ended
-from test_gear_methods import Case
+from test_one_gear import Case
 
 CASES = LOGS.parent / "cases"
 # Where identify names no gear, the law is asked at these ratios: of data sheets, or as the logs were simulated.

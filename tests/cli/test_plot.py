@@ -134,23 +134,3 @@ class Plots(Case):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertTrue((self.folder / name).is_file())
         self.assertFalse((self.folder / "pwned").exists())
-
-    def test_without_gnuplot_the_result_and_the_figure_s_data_are_written_and_it_is_said(self):
-        ended(4, self.plot(COMMANDS["spectrum"], "picture.svg", PATH="/nowhere"), "no gnuplot", "gnuplot-nox")
-        self.assertTrue((self.folder / "result").read_text().startswith("2 lines in "))
-        self.assertEqual(json.loads((self.folder / "picture.json").read_text())["name"], "spectrum")
-        self.assertFalse((self.folder / "picture.svg").exists())
-        terminal = run(*COMMANDS["spectrum"], "--bins", "--plot", "-", environment={"PATH": "/nowhere"})
-        self.assertEqual((terminal.returncode, terminal.stdout), (4, ""))
-
-    def test_a_gnuplot_that_fails_is_quoted(self):
-        fake = self.folder / "gnuplot"
-        fake.write_text("#!/bin/sh\necho 'it hurts' >&2\nexit 3\n")
-        fake.chmod(0o755)
-        ended(4, self.plot(COMMANDS["candidate-table"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin"), "it hurts")
-
-    def test_a_start_that_fails_only_in_the_child_is_no_gnuplot(self):
-        fake = self.folder / "gnuplot"
-        fake.write_text("#!/bin/sh\nexit 127\n")
-        fake.chmod(0o755)
-        ended(4, self.plot(COMMANDS["spectrum"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin"), "no gnuplot")

@@ -4,7 +4,7 @@
 import json
 
 from commands import COMMANDS, DATA, WRITES_A_LOG, asked
-from test_gear_methods import MOVE, Case
+from test_one_gear import MOVE, Case
 
 PAPER_90 = DATA / "paper_90deg_s.csv"
 LOW = ["--method", "lowpass,cutoff=13rad/s"]

@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""simulate: the logs of data/ byte for byte, seeds, formats, and what it refuses."""
+"""simulate: the logs of data/ byte for byte, and noise that is correlated."""
 
 import csv
 import math
 import os
-import pathlib
 import subprocess
 import unittest
 
 from commands import DATA, SOURCE, TOOL, Case, ended, run
-
-JOINT = ["--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--inertia", "0.5kgm2"]
-MOVE = ["--motion", "poly6,to=90deg,duration=1s", "--motion", "constant,speed=60deg/s,duration=0.5s",
-        "--sample-rate", "1kHz"]
 
 
 def simulate(*words, stdin=None):
@@ -72,44 +67,7 @@ class Data(Case):
         self.assertLess(sum(path.stat().st_size for path in DATA.iterdir()), 1_500_000)
 
 
-class Seeds(unittest.TestCase):
-    def test_noise_on_one_column_leaves_every_other_as_it_was(self):
-        plain, torque, both = (simulate(*JOINT, *MOVE, *noise) for noise in (
-            [], ["--noise", "0.05Nm"], ["--noise", "0.05Nm", "--velocity-noise", "0.15deg/s"]))
-        self.assertEqual(column(torque, "velocity_deg_s"), column(plain, "velocity_deg_s"))
-        self.assertEqual(column(both, "torque_nm"), column(torque, "torque_nm"))
-        self.assertEqual(column(both, "position_deg"), column(plain, "position_deg"))
-        self.assertNotEqual(column(both, "velocity_deg_s"), column(plain, "velocity_deg_s"))
-
-
-class AlongLogs(Case):
-    """simulate LOG: the model along the motion that a log measured."""
-
-    JOINT = ["--gear-ratio", "100", "--inertia", "0.5kgm2", "--ripple", "1:0.8Nm:30deg", "--effect",
-             "viscous-friction,coefficient_nm_per_deg_s=0.005"]
-    MOVES = ["--motion", "rest,duration=0.3s", "--motion", "poly6,to=120deg,duration=1s", "--motion",
-             "rest,duration=0.3s", "--motion", "poly6,to=-20deg,duration=1.5s", "--motion", "rest,duration=0.3s",
-             "--sample-rate", "1kHz"]
-
-    def log(self, *words, moves=None):
-        path = str(self.folder / "log.csv")
-        ended(0, simulate(*self.JOINT, *(moves or self.MOVES), *words, "-o", path, "--force"))
-        return path
-
-    def test_units_joints_and_pipes_are_read_as_every_command_does(self):
-        log = pathlib.Path(self.log())
-        done = simulate(*self.JOINT, str(log))
-        lines = log.read_text().splitlines()
-        odd = [lines[0].replace("velocity_deg_s", "j4_velocity [rad/s]").replace("torque_nm", "j4_torque [Nm]")
-               .replace("position_deg", "j4_position [deg]")]
-        for line in lines[1:]:
-            cells = line.split(",")
-            cells[1] = repr(math.radians(float(cells[1])))
-            odd.append(",".join(cells))
-        piped = simulate(*self.JOINT, "--joint", "j4", "-", stdin="\n".join(odd).encode())
-        for a, b in zip(column(piped, "torque_nm"), column(done, "torque_nm")):
-            self.assertAlmostEqual(a, b, delta=1e-9)
-
+class Noise(unittest.TestCase):
     def test_correlated_noise_has_its_rms_and_its_correlation(self):
         long = ["--gear-ratio", "1", "--motion", "rest,duration=40s", "--sample-rate", "1kHz", "--noise", "50mNm"]
         values = column(simulate(*long, "--noise-correlation", "0.9"), "torque_nm")

@@ -59,16 +59,6 @@ class Streams(Case):
             ended(0, self.run_with(words, preexec_fn=lambda: [os.close(stream) for stream in (0, 1, 2)]))
             self.assertEqual((self.folder / "out.csv").read_bytes(), usual)
 
-    def test_closed_input_and_output_are_errors_with_a_name(self):
-        ended(4, self.run_with(("info", "log.csv"), stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1)), b"standard output: cannot write")
-        ended(4, subprocess.run([TOOL, "info", "-"], cwd=self.folder, capture_output=True, preexec_fn=lambda: os.close(0)),
-              b"standard input: cannot read")
-
-    def test_help_that_cannot_be_written_is_an_error(self):
-        for words in (("--help",), ("--version",), ("info", "--help")):
-            with open("/dev/full", "w") as full:
-                self.assertEqual(self.run_with(words, stdout=full, stderr=subprocess.PIPE).returncode, 4, words)
-
 
 # The library in a page of report, which is a megabyte; what came in is in the scripts that are shorter.
 PLOTLY = re.compile(r"<script>(?:(?!</script>).){500000,}</script>", re.S)

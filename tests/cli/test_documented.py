@@ -1,15 +1,75 @@
 # SPDX-License-Identifier: MIT
-"""docs/paper.md: made again by scripts/reproduce-paper and compared, and what the figures must show."""
+"""The pictures of the documentation show what the tool shows today: compared by their data, not by their pixels."""
 
 import csv
 import importlib.machinery
 import importlib.util
+import json
+import math
+import os
+import pathlib
+import re
 import subprocess
 import sys
 import unittest
 
-from commands import SOURCE, ended
+from commands import SOURCE, TOOL, ended, run, Case
 
+FIGURES = SOURCE / "docs" / "figures"
+
+
+def alike(kept, made, path=""):
+    """Where two documents differ, or None. Numbers may differ in their last digits: another compiler, another cosine."""
+    if isinstance(kept, dict) and isinstance(made, dict):
+        if kept.keys() != made.keys():
+            return f"{path}: fields {sorted(kept)} and {sorted(made)}"
+        return next(filter(None, (alike(kept[k], made[k], f"{path}.{k}") for k in kept)), None)
+    if isinstance(kept, list) and isinstance(made, list):
+        if len(kept) != len(made):
+            return f"{path}: {len(kept)} and {len(made)} entries"
+        return next(filter(None, (alike(a, b, f"{path}[{i}]") for i, (a, b) in enumerate(zip(kept, made)))), None)
+    number = (int, float)
+    if isinstance(kept, number) and isinstance(made, number) and not isinstance(kept, bool):
+        return None if math.isclose(kept, made, rel_tol=1e-5, abs_tol=1e-6) else f"{path}: {kept} and {made}"
+    return None if kept == made else f"{path}: {kept!r} and {made!r}"
+
+
+class Figures(Case):
+    def test_every_picture_shows_what_its_command_shows_today(self):
+        ended(0, subprocess.run([SOURCE / "scripts" / "make-figures", self.folder], capture_output=True, timeout=120,
+                                env=dict(os.environ, ONLY_DATA="1")))
+        made = {path.name: json.loads(path.read_text()) for path in self.folder.glob("*.json")}
+        kept = {path.name: json.loads(path.read_text()) for path in FIGURES.glob("*.json")}
+        self.assertEqual(sorted(kept), sorted(made))
+        for name in kept:
+            kept[name].pop("version"), made[name].pop("version")
+            self.assertIsNone(alike(kept[name], made[name], name), "run scripts/make-figures and look at the pictures")
+
+    def test_every_picture_on_a_page_is_there_with_its_data(self):
+        for page in (FIGURES / "README.md", SOURCE / "README.md"):
+            names = re.findall(r"!\[[^]]+\]\(([^)]+\.png)\)", page.read_text())
+            self.assertTrue(names, page)
+            for name in names:
+                picture = page.parent / name
+                self.assertTrue(picture.with_suffix(".json").is_file(), name)
+                self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n", name)
+
+    def test_every_listed_figure_is_on_the_page_and_in_its_command_s_help(self):
+        listed = re.findall(r'^FIGURE\("([\w-]+)", "(\w+)"\)', (SOURCE / "src" / "figure" / "figures.def").read_text(), re.M)
+        shown = re.findall(r"!\[[^]]+\]\(([^)]+)\.png\)", (FIGURES / "README.md").read_text())
+        names = [json.loads((FIGURES / f"{name}.json").read_text())["name"] for name in shown]
+        for name, command in listed:
+            self.assertIn(name, names, f"docs/figures/README.md has no picture of figure {name}")
+            help_text = run(command, "--help-all").stdout
+            self.assertRegex(help_text, rf"as a picture \([^)]*\b{name}\b", command)
+        self.assertEqual(set(names), {name for name, _ in listed}, "src/figure/figures.def")
+
+    def test_pictures_are_small(self):
+        for path in FIGURES.glob("*.png"):
+            self.assertLess(path.stat().st_size, 300_000, path.name)
+
+
+# docs/paper.md: made again by scripts/reproduce-paper and compared, and what the figures must show.
 SCRIPT = SOURCE / "scripts" / "reproduce-paper"
 PAPER = SOURCE / "docs" / "paper"
 
@@ -44,7 +104,7 @@ class Page(unittest.TestCase):
         self.assertFalse(same("1\n2\n", "1\n"))
 
 
-class Figures(unittest.TestCase):
+class PaperFigures(unittest.TestCase):
     def test_lines_lie_where_the_paper_read_them_off_its_plots(self):
         for row in rows("figure2.csv"):
             if row["speed_deg_s"] == "0":
@@ -102,3 +162,18 @@ class Move(unittest.TestCase):
                 self.assertEqual(row["switches"], "16")
             elif not row["guard"]:
                 self.assertGreater(int(row["switches"]), 100)
+
+
+# docs/certificate.md is what scripts/certify measures today, and it quotes README.
+PYTHONS = [python for python in (sys.executable, "/usr/bin/python3")
+           if pathlib.Path(python).exists() and not subprocess.run([python, "-c", "import scipy"], capture_output=True).returncode]
+
+
+class Certificate(unittest.TestCase):
+    @unittest.skipUnless(PYTHONS, "no SciPy")
+    def test_the_page_is_not_stale(self):
+        """Rows whose oracle is not there are skipped; certify names them."""
+        done = subprocess.run([PYTHONS[0], SOURCE / "scripts/certify", "--check"], env={"RIPPLENOTCH": TOOL, "PATH": "/usr/bin:/bin"},
+                              capture_output=True, text=True)
+        print(*(line for line in done.stderr.splitlines() if "SKIPPED" in line), sep="\n")
+        self.assertEqual(done.returncode, 0, done.stderr)
