@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/gear_ratio.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Motion as a log has it: between the steps of an encoder, with a velocity that is off, steady and at rest.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>

@@ -9,7 +9,6 @@
 #include <complex>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <random>
