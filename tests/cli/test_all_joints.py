@@ -126,8 +126,3 @@ class Currents(Case):
                 with_constant = self.good(*words, "--kt", "2").stdout
                 self.assertIn("Nm", with_constant)
                 self.assertNotIn("torque_unit", json.loads(self.good(*words, "--kt", "2", "--json").stdout)["recording"])
-
-    def test_the_columns_of_a_table_keep_their_places(self):
-        amps = self.good("spectrum", "amps.csv", "--joint", "j1", "-q").stdout
-        newton_metres = self.good("spectrum", "amps.csv", "--joint", "j1", "-q", "--kt", "1").stdout
-        self.assertEqual([len(line) for line in amps.splitlines()[1:3]], [len(line) for line in newton_metres.splitlines()[1:3]])

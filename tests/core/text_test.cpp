@@ -267,11 +267,6 @@ TEST_CASE("the shortest text of usual numbers is the formatting library's") {
     CHECK(counted.taken > 1200000);
 }
 
-// The same for half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
-TEST_CASE("the shortest text of forty million usual numbers is the formatting library's", "[.kernels]") {
-    for (std::uint64_t seed = 10; seed < 50; ++seed) CHECK(compare(seed, 1000000).wrong == 0);
-}
-
 TEST_CASE(
     "a tie of two shortest texts goes to the even digit, signs and whole numbers are as they are written") {
     std::vector<char> room(32);
@@ -374,11 +369,6 @@ void check_numbers(std::uint64_t seed, std::size_t count) {
 
 TEST_CASE("numbers with fixed decimals are printf's, whatever their size and their decimals") {
     check_numbers(23, 35000);
-}
-
-// The same for half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
-TEST_CASE("forty million numbers with fixed decimals are printf's", "[.kernels]") {
-    for (std::uint64_t seed = 1000; seed < 10000; seed += 1000) check_numbers(seed, 250000);
 }
 
 TEST_CASE("ties, signs, zeros and what is no number are printed as printf does") {

@@ -162,11 +162,6 @@ TEST_CASE("numbers of many rows at once are those of the careful reader, bit for
     for (std::uint64_t seed = 7; seed < 10; ++seed) CHECK(misread(seed, 100000) == 0);
 }
 
-// The same for half a minute: ctest leaves it out, `test_log "[.kernels]"` runs it.
-TEST_CASE("thirty million numbers at once are those of the careful reader, bit for bit", "[.kernels]") {
-    for (std::uint64_t seed = 100; seed < 200; ++seed) CHECK(misread(seed, 100000) == 0);
-}
-
 TEST_CASE("a byte that is not as it was is read as the careful way reads it, wherever it stands", "[log]") {
     std::mt19937_64 random(11);
     const std::string_view junk = "0123456789.,-+eE \r\n\"x;:/\t";
