@@ -266,8 +266,6 @@ def identify(path, *options):
 
 
 class OneLogInManyDialects(Case):
-    def test_there_are_more_than_thirty_four(self):
-        self.assertGreaterEqual(len(DIALECTS), 34)
 
     def test_right_or_refused_with_the_option_that_makes_it_right(self):
         right, refused = [], []

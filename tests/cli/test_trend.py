@@ -127,11 +127,6 @@ class Determinism(Case):
         self.assertEqual(first, second)
         self.assertEqual(first, third)
 
-    def test_the_seed_is_told_and_the_same_seed_gives_the_same_bytes(self):
-        text = text_of(lines_of(fleet.fleet(4, 40, 22, events=True)))
-        self.assertEqual(trend("-", "--json", "--seed", "7", text=text).stdout, trend("-", "--json", "--seed", "7", text=text).stdout)
-        self.assertEqual(json.loads(trend("-", "--json", "--seed", "7", text=text).stdout)["seed"], 7)
-
     @unittest.skipIf(sanitized(TOOL), "sanitizers take their own time")
     def test_ten_thousand_lines_take_at_most_two_seconds_of_a_core(self):
         path = self.folder / "many.ndjson"
