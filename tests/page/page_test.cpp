@@ -390,9 +390,10 @@ TEST_CASE("a diagnosis has its verdict in words, the gap as a figure and its par
     CHECK(section_of(full).verdict == full.doubt);
     full.doubt.clear();
     const PageSection section = section_of(full);
-    CHECK(section.verdict ==
-          "Missing: quantization, coulomb-friction 0.4999 +/- 0.0011 Nm, tone or ripple; residual 0.435 to "
-          "0.0475 Nm rms, noise 0.0474 Nm rms.");
+    CHECK(
+        section.verdict ==
+        "Missing: coulomb-friction 0.4999 +/- 0.0011 Nm, tone or ripple; the log has quantization; residual "
+        "0.435 to 0.0475 Nm rms, noise 0.0474 Nm rms.");
     REQUIRE(section.figures.size() == 1);
     const Panel& panel = section.figures[0].panels[0];
     CHECK(panel.curves[0].y == std::vector<double>{0.434974, 0.0496759, 0.0475});
