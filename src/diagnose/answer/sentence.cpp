@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -21,10 +20,10 @@ std::string size_text(const Finding& finding) {
         if (effect.parameters[p].left_out == LeftOut::refused)
             text += fmt::format(" {} {:.4g}", effect.parameters[p].name, *finding.term.values[p]);
     }
-    // Of several factors the one that its error leaves least in doubt.
+    // Of several factors the first whose interval does not hold 0.
     const auto rank = [&](const FittedValue& value) {
         return std::pair(effect.parameters[value.parameter].linear,
-                         std::abs(value.value) / value.standard_error.value_or(std::abs(value.value)));
+                         !value.ci95 || value.ci95->low > 0.0 || value.ci95->high < 0.0);
     };
     const FittedValue* size = nullptr;
     for (const FittedValue& value : finding.values)
