@@ -103,7 +103,7 @@ ExitCode give(const Answer& answer, const CommonOptions& common) {
         write_text(file.path, file.text, common.overwrite());
         if (!file.said.empty()) say(common, file.said);
     }
-    if (answer.beside_output) {
+    if (answer.own_output) {
         if (answer.format != nullptr) write_columns(answer, common.output, common);
         const std::string text = common.json && answer.document ? answer.document() : answer.text;
         if (!text.empty()) write_text("-", text, ByteSink::Overwrite::no);

@@ -40,7 +40,7 @@ struct Answer {
     std::vector<NumberColumn> columns = {};
     const LogFormat* format = nullptr;
     /// -o has something else (a log, exported code): text and document go to standard output.
-    bool beside_output = false;
+    bool own_output = false;
     std::vector<File> files = {};
     std::vector<std::string> complaints = {};  ///< lines on standard error when all is written
     std::string joint = {};                    ///< that it is about, where the log names it

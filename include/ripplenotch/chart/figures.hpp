@@ -56,14 +56,10 @@ struct MapLines {
 
 // Orders along a log, ripple maps, and a torque before and after a filter.
 
-// A ripple map: amplitude and phase of each order over speed, by direction.
-
-/// Curves of the mean over the joint's turn, at the middle load; ribbons of 95 % by the errors of the values
-/// at the speeds, taken as independent. Two panels, empty for an empty map.
+/// A ripple map, amplitude and phase of each order over speed, by direction: curves of the mean over the
+/// joint's turn, at the middle load; ribbons of 95 % by the errors of the values at the speeds, taken as
+/// independent. Two panels, empty for an empty map.
 [[nodiscard]] Figure map_figure(const std::string& source, const MapFit& fit);
-
-// Torque before and after a filter along a log of any length, in bounded memory, and the ledger of its
-// switches.
 
 /// One sample, before and after a filter.
 struct CourseSample {
@@ -89,6 +85,8 @@ class CloseUp {
     std::size_t ended_ = 0;
 };
 
+/// Torque before and after a filter along a log of any length, in bounded memory, with the ledger of its
+/// switches.
 class TorqueCourse {
   public:
     /// In the order of the log.
@@ -143,8 +141,7 @@ inline constexpr double lowest_magnitude_db = -120.0;
 // Methods side by side: frequency responses, a step and a ramp; on a log whose true torque is known, their
 // outputs.
 
-// The outputs of the methods for a log whose true torque is known, in bounded memory.
-
+/// The outputs of the methods for a log whose true torque is known, in bounded memory.
 class ComparedCourse {
   public:
     /// As ComparedLog::watch calls it. `truth_nm` has a value for each row of the block.

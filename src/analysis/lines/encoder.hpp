@@ -22,8 +22,8 @@ std::size_t take_off_encoder_lines(std::span<const TraceView> logs, const SweepR
 /// The angle of a position between the steps of its encoder, as it was logged where these are too fine to
 /// matter. Rounding to steps makes lines of its own: order o of amplitude A is seen as well at k N + o and
 /// k N - o with A o / (k N), N steps per turn, folded at the sample rate. Quadratics over half-overlapping
-/// windows, each as long as what it leaves of the logged angle is no more
-/// than rounding leaves; the logged angle where none is. O(n log n).
+/// windows, each as long as what it leaves of the logged angle is no more than rounding leaves; the logged
+/// angle where none is. O(n log n).
 [[nodiscard]] OutputAngle between_steps(const TraceView& log, std::vector<double> logged_turns);
 
 }  // namespace ripplenotch

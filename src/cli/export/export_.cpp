@@ -74,10 +74,10 @@ ReadBack read_back(const Written& written, const CommonOptions& common) {
 }
 
 // What was found out about it: on standard output, unless the file itself went there.
-Answer told(const std::string& text, const CommonOptions& common) {
-    const bool beside = common.output != "-";
-    if (!beside && common.verbose) talk_lines(text);
-    return {.text = beside ? text : "", .beside_output = true};
+Answer shown(const std::string& text, const CommonOptions& common) {
+    const bool is_free = common.output != "-";
+    if (!is_free && common.verbose) talk_lines(text);
+    return {.text = is_free ? text : "", .own_output = true};
 }
 
 // Where a generated file is from, and whose it is.
@@ -198,12 +198,12 @@ Answer export_code(const ExportRequest& request, const Contender& method, const 
     const LoadedCode code = read_method_code(again.bytes, again.source, design, settings);
     const CodeCheck check = run_beside(method, *request.sample_rate, design, code);
     return within_tolerance(
-        told(fmt::format(
-                 "{}: {}, read back and compared with the method over {} samples in {}.\nlargest output     "
-                 "     {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
-                 again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
-                 check.largest_error_nm),
-             request.common),
+        shown(fmt::format(
+                  "{}: {}, read back and compared with the method over {} samples in {}.\nlargest output     "
+                  "     {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
+                  again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
+                  check.largest_error_nm),
+              request.common),
         check.largest_error_nm, check.largest_nm, "largest output", request.tolerance_percent);
 }
 
@@ -247,12 +247,12 @@ Answer export_map(const ExportRequest& request, const std::string& command_line)
     const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
     const MapCheck check = verify_map_export(map, loaded);
     return within_tolerance(
-        told(fmt::format(
-                 "{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm rms\n"
-                 "not representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
-                 again.source, target.name, check.states, loaded.arithmetic, check.ripple_nm,
-                 check.not_held_nm, check.largest_error_nm),
-             request.common),
+        shown(fmt::format(
+                  "{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm rms\n"
+                  "not representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
+                  again.source, target.name, check.states, loaded.arithmetic, check.ripple_nm,
+                  check.not_held_nm, check.largest_error_nm),
+              request.common),
         check.largest_error_nm, check.ripple_nm, "map's ripple, rms", request.tolerance_percent);
 }
 
@@ -284,7 +284,7 @@ Answer export_model(const ExportRequest& request, const std::string& command_lin
     for (const MjcfPart& part : written.not_held)
         text += fmt::format("not held: {}: {}\n", part.effect, part.words);
     if (model.ripple) text += "not held: ripple_map: export it from map.json\n";
-    return told(text, request.common);
+    return shown(text, request.common);
 }
 
 // What was read back, for people.
@@ -441,7 +441,7 @@ Answer run_export(const ExportRequest& request, const std::string& command_line)
     report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
     report.violations = export_violations(report.checks, request.tolerance_percent);
 
-    Answer answer = told(export_report_to_text(report), request.common);
+    Answer answer = shown(export_report_to_text(report), request.common);
     add_violations(report, answer);
     answer.document = [report = std::move(report), provenance] {
         return export_report_to_json(report, provenance);

@@ -477,7 +477,7 @@ Answer run_filter(FilterRequest& request, const std::string& command_line) {
     }
     std::vector<StreamReport> reports =
         stream.run(runs, watched ? watched.get() : writer.get(), threads_of(request));
-    Answer answer{.beside_output = true};
+    Answer answer{.own_output = true};
     for (std::size_t j = 0; j < works.size(); ++j) {
         works[j].metrics.stream = std::move(reports[j]);
         if (const std::string against = against_gear_of(request, works[j], read); !against.empty())

@@ -296,7 +296,7 @@ Answer simulate(const SimulateOptions& options) {
     Progress::current().begin("simulating", "", 0);
     const auto gap = followed(options, model, course);
     Answer answer{
-        .columns = make_columns(options, model, std::move(course)), .format = &format, .beside_output = true};
+        .columns = make_columns(options, model, std::move(course)), .format = &format, .own_output = true};
     const auto& columns = answer.columns;
     say(options.common, fmt::format("{} rows of {} columns at {} Hz as {}", columns[0].values.size(),
                                     columns.size(), shortest(sample_rate.value()), format.name));

@@ -85,16 +85,16 @@ void add_windows(const TraceView& log, std::size_t number, MapData& data) {
                                     fit.weight() * samples / (samples - static_cast<double>(fit.unknowns()));
             const double of_fit = 4.0 * variance * squares / (fit.weight() * fit.weight());
             for (std::size_t i = 0; i < lines.size(); ++i) {
-                double beside = 0.0, places = 0.0;
+                double near = 0.0, places = 0.0;
                 for (const double aside : {-beside_turns, beside_turns}) {
                     const double power =
                         fit.power_beside(torque, {lines[i].order + aside, turns}, clear_of_others * size);
                     if (std::isnan(power)) continue;
-                    beside += power;
+                    near += power;
                     places += 1.0;
                 }
                 window.value.push_back(std::conj(fit.amplitude(torque, i)));
-                window.noise.push_back(std::max(places > 0.0 ? beside / places : 0.0, of_fit));
+                window.noise.push_back(std::max(places > 0.0 ? near / places : 0.0, of_fit));
             }
         }
     }
